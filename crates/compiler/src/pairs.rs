@@ -101,18 +101,37 @@ pub struct Tables {
 }
 
 impl Tables {
-    /// Numbers that are needed for M̄, its factors and what is solved for, so many, and for what else is made on the way.
+    /// Columns of what is solved with M̄, where something is.
+    pub const fn solved_columns(&self) -> Option<usize> {
+        match self.product {
+            Product::Mass | Product::Inverse | Product::SecondInverse => None,
+            Product::InverseMass | Product::Forward => Some(self.size[1]),
+            Product::SecondForward => Some(self.places.sizes[0]),
+        }
+    }
+
+    /// Numbers that are needed beside those for solutions, so many.
     pub fn room(&self, solution: usize) -> usize {
         let [freedoms, speeds] = self.places.sizes;
         let width = self.size[1];
         match self.product {
-            Product::Mass | Product::Inverse | Product::SecondInverse => 0,
-            Product::InverseMass | Product::Forward => solution,
             Product::SecondForward => {
-                let twice = 4 * (freedoms + speeds).pow(2);
-                solution + speeds * (width + freedoms) + width + twice
+                solution + speeds * width + width + 4 * (freedoms + speeds).pow(2)
             }
+            _ => solution,
         }
+    }
+
+    /// Numbers that loops of one state need room for.
+    pub fn room_of_one(&self) -> usize {
+        let solution = |columns| self.room(room_to_solve(self.above.len(), columns));
+        self.solved_columns().map_or(0, solution)
+    }
+
+    /// Numbers of eight states that loops side by side need room for.
+    pub fn room_of_lanes(&self) -> usize {
+        self.solved_columns()
+            .map_or(0, |_| room_in_lanes(self.above.len()))
     }
 
     /// For each speed those towards the root, the nearest first, in ranges of speeds that follow each other.
@@ -159,7 +178,7 @@ impl Tables {
     pub fn evaluate(&self, work: &[f64]) -> Vec<f64> {
         let [rows, width] = self.size;
         let mut results = vec![0.0; rows * width];
-        let mut room = vec![0.0; self.room(room_to_solve(self.above.len()))];
+        let mut room = vec![0.0; self.room_of_one()];
         self.with_pairs(|pairs| match self.product {
             Product::Mass => pairs.mass(work, &mut results),
             Product::InverseMass => {
@@ -181,7 +200,7 @@ impl Tables {
     pub fn evaluate_in_lanes(&self, work: &[Lanes]) -> Vec<Lanes> {
         let [rows, width] = self.size;
         let mut results = vec![Lanes::default(); rows * width];
-        let mut factors = vec![Lanes::default(); self.room(room_in_lanes(self.above.len()))];
+        let mut factors = vec![Lanes::default(); self.room_of_lanes()];
         let columns = self.strips(work.len());
         let strips = columns.iter().map(|strip| Strip {
             columns: strip.columns,
@@ -238,7 +257,7 @@ impl Tables {
             count.multiplications += terms;
             count.additions += terms + 2 * freedoms * width;
         }
-        if self.room(1) > 0 {
+        if self.solved_columns().is_some() {
             self.solution(&mut count);
         }
         count

@@ -124,8 +124,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 9], v: &[T; 6], tau: &[T; 6]) -> [T; 
 ///
 /// Operations: 38 additions, 59 multiplications, 2 divisions, 4 function calls.
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
-#[must_use]
-pub fn momentum_rates<T: Scalar>(q: &[T; 9], p: &[T; 6], tau: &[T; 6]) -> [[T; 6]; 2] {
+pub fn momentum_rates_into<T: Scalar>(q: &[T; 9], p: &[T; 6], tau: &[T; 6], rows: &mut [[T; 6]; 2]) {
     let n = T::from_f64;
     // all joints: sines and cosines (4 function calls)
     let (sines, cosines) = T::sin_cos_all(&[q[7], q[8]]);
@@ -205,10 +204,18 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 9], p: &[T; 6], tau: &[T; 6]) -> [[T; 6
                 .mul_add(front_momentum_rate_4, front_cos.mul_add(board_momentum_4, tau[1] + board_momentum_rate)),
         ),
     );
-    [
+    *rows = [
         [board_composite_inertia_5, board_composite_inertia_4, board_composite_inertia_6, p[3], p[4], p[5]],
         [n(0.0), board_momentum_rate_2, n(0.0), tau[3], tau[4], tau[5]],
-    ]
+    ];
+}
+
+/// Returns what [`momentum_rates_into`] assigns.
+#[must_use]
+pub fn momentum_rates<T: Scalar>(q: &[T; 9], p: &[T; 6], tau: &[T; 6]) -> [[T; 6]; 2] {
+    let mut rows = [[T::zero(); 6]; 2];
+    momentum_rates_into(q, p, tau, &mut rows);
+    rows
 }
 
 /// H = ½ p̄ᵀ M̄⁻¹ p̄ + V, J.

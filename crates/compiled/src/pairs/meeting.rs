@@ -41,50 +41,61 @@ pub(super) fn meet<T: Scalar, const N: usize>(
     own: &[T; N],
     columns: Columns<'_, T>,
     (rows, width): (&mut [T], usize),
-    sign: impl Fn(T) -> T,
+    sign: impl Fn(T) -> T + Copy,
 ) {
     let [from, to] = meeting.columns;
+    let count = to - from;
     let row = &mut rows[meeting.row * width + from..];
-    for place in (0..to - from).step_by(EIGHT) {
-        let others = meeting.others + place;
-        eight(&mut row[place..], |entries| {
-            products(own, columns, others, entries, &sign)
+    let Some(entries) = row.get_mut(..count + EIGHT) else {
+        meet_last(own, columns, meeting.others, &mut row[..count], sign);
+        return;
+    };
+    let blocks = count.div_ceil(EIGHT);
+    let components: [&[[T; EIGHT]]; N] =
+        core::array::from_fn(|i| columns.blocks(meeting.others, i, blocks));
+    for (place, block) in entries.as_chunks_mut::<EIGHT>().0[..blocks]
+        .iter_mut()
+        .enumerate()
+    {
+        let numbers: [&[T; EIGHT]; N] = core::array::from_fn(|i| &components[i][place]);
+        *block = core::array::from_fn(|column| {
+            let mut sum = own[0] * numbers[0][column];
+            for i in 1..N {
+                sum = own[i].mul_add(numbers[i][column], sum);
+            }
+            sign(sum)
         });
     }
-    eight(&mut row[to - from..], |entries| {
-        *entries = [T::zero(); EIGHT]
-    });
+    if let Some(behind) = entries.last_chunk_mut::<EIGHT>() {
+        *behind = [T::zero(); EIGHT];
+    }
 }
 
-/// Products of a row's own numbers with those of eight columns.
-#[inline(always)]
-fn products<T: Scalar, const N: usize>(
+/// Assigns the entries of a meeting one by one: those in the last row, behind which there are no eight.
+#[cold]
+#[inline(never)]
+fn meet_last<T: Scalar, const N: usize>(
     own: &[T; N],
-    Columns { work, stride }: Columns<'_, T>,
+    columns: Columns<'_, T>,
     others: usize,
-    entries: &mut [T; EIGHT],
+    entries: &mut [T],
     sign: impl Fn(T) -> T,
 ) {
-    let components: [&[T; EIGHT]; N] =
-        core::array::from_fn(|i| super::numbers(work, others + stride * i));
     for (column, entry) in entries.iter_mut().enumerate() {
-        let mut sum = own[0] * components[0][column];
-        for i in 1..N {
-            sum = own[i].mul_add(components[i][column], sum);
-        }
+        let number = |i| columns.work[others + column + columns.stride * i];
+        let products = own.iter().enumerate().skip(1);
+        let sum = products.fold(own[0] * number(0), |sum, (i, own)| {
+            own.mul_add(number(i), sum)
+        });
         *entry = sign(sum);
     }
 }
 
-/// Assigns the first eight entries, or as many as there are.
-#[inline(always)]
-fn eight<T: Scalar>(row: &mut [T], assign: impl Fn(&mut [T; EIGHT])) {
-    match row.first_chunk_mut() {
-        Some(entries) => assign(entries),
-        None => {
-            let mut entries = [T::zero(); EIGHT];
-            assign(&mut entries);
-            row.copy_from_slice(&entries[..row.len()]);
-        }
+impl<'a, T> Columns<'a, T> {
+    /// A component of columns from one on, eight columns a block.
+    #[inline(always)]
+    fn blocks(&self, others: usize, component: usize, blocks: usize) -> &'a [[T; EIGHT]] {
+        let numbers = &self.work[others + self.stride * component..][..blocks * EIGHT];
+        numbers.as_chunks().0
     }
 }

@@ -5,7 +5,7 @@
 //! loops over tables. What no path of the tree connects stays 0.
 //!
 //! [`Pairs`] are the tables; `work` holds the numbers of one state, as [`Places`] says. Numbers that columns beside each other need stand beside each other, so that
-//! compilers vectorise: eight columns of a row are found at once, and M̄⁻¹ is multiplied by up to 48 columns at once.
+//! compilers vectorise: eight columns of a row are found at once, and M̄⁻¹ is multiplied by up to 48 columns at once, in rows that begin where lines of the cache do.
 
 mod lanes;
 mod meeting;
@@ -137,18 +137,20 @@ impl Pairs<'_> {
         }
     }
 
-    /// M̄⁻¹ by rows, into zeros; rows of rates that are given are 0. `room` has what [`room_to_solve`] says.
+    /// M̄⁻¹ by rows; rows of rates that are given are 0. `room` has as many zeros as [`room_to_solve`] says.
     pub fn inverse_mass<T: Scalar>(&self, work: &[T], room: &mut [T], rows: &mut [T]) {
         let size = self.size();
+        let (mut factors, mut sides) = self.split(room, size);
         for speed in 0..size {
             let given = self.held.iter().any(|&[held, _]| held == speed);
-            rows[speed * size + speed] = if given { T::zero() } else { T::one() };
+            let place = speed * sides.stride + speed;
+            sides.entries[place] = if given { T::zero() } else { T::one() };
         }
-        let (mut factors, strip) = self.split(room);
         self.fill_mass(work, factors.entries, factors.stride);
         self.fix(&mut factors);
         self.factorise(&mut factors);
-        self.solve(&factors, strip, rows, size);
+        self.solve(&factors, &mut sides);
+        self.finish(&sides, rows, size);
     }
 
     /// Rows of derivatives of inverse dynamics, into zeros: in all degrees of freedom, then in all speeds.
@@ -156,19 +158,20 @@ impl Pairs<'_> {
         self.fill_slopes(work, rows, self.places.width(), |entry| entry);
     }
 
-    /// Rows of derivatives of forward dynamics, `width` numbers each, into zeros: in all degrees of freedom, in all speeds, in all efforts, and the rates.
-    /// `room` has what [`room_to_solve`] says.
+    /// Rows of derivatives of forward dynamics, `width` numbers each: in all degrees of freedom, in all speeds, in all efforts, and the rates.
+    /// `room` has as many zeros as [`room_to_solve`] says.
     pub fn forward<T: Scalar>(&self, work: &[T], room: &mut [T], rows: &mut [T], width: usize) {
-        self.right_hand_sides(work, rows, width);
-        let (mut factors, strip) = self.split(room);
+        let (mut factors, mut sides) = self.split(room, width);
+        self.right_hand_sides(work, sides.entries, sides.stride);
         self.fill_mass(work, factors.entries, factors.stride);
-        self.hold(&mut factors, rows, width);
+        self.hold(&mut factors, &mut sides, width - 1);
         self.factorise(&mut factors);
-        self.solve(&factors, strip, rows, width);
+        self.solve(&factors, &mut sides);
+        self.finish(&sides, rows, width);
         add(self.followed, work, rows, width);
     }
 
-    /// What forward dynamics is solved for: opposites of derivatives of inverse dynamics, S̄ᵀ and the rates.
+    /// What forward dynamics is solved for, in rows of zeros `width` apart: opposites of derivatives of inverse dynamics, S̄ᵀ and the rates.
     pub fn right_hand_sides<T: Scalar>(&self, work: &[T], rows: &mut [T], width: usize) {
         // Zeros stay positive, so that it does not show whether they are skipped.
         self.fill_slopes(work, rows, width, |entry| T::zero() - entry);
@@ -179,9 +182,8 @@ impl Pairs<'_> {
         self.places.sizes[1]
     }
 
-    /// M̄ on and left of the diagonal, by rows of `stride` numbers, all of which are assigned.
+    /// M̄ on and left of the diagonal, by rows of `stride` numbers, into zeros.
     fn fill_mass<T: Scalar>(&self, work: &[T], matrix: &mut [T], stride: usize) {
-        matrix[..self.size() * stride].fill(T::zero());
         let columns = Columns {
             work,
             stride: self.places.column_stride(),

@@ -15,8 +15,8 @@ impl Pairs<'_> {
         self.fill_bends(work, rows, width);
     }
 
-    /// The Hessian of contracted forward dynamics by rows of `width`, over (ϕ, v̄, τ); `room` has what [`super::room_to_solve`] says and, with S speeds and K degrees
-    /// of freedom, `S width + S K + width + 4 (K + S)²` numbers.
+    /// The Hessian of contracted forward dynamics by rows of `width`, over (ϕ, v̄, τ); `room` has zeros: with S speeds and K degrees of freedom as many as
+    /// [`super::room_to_solve`] says for K columns, and `S width + width + 4 (K + S)²`.
     pub fn second_forward<T: Scalar>(
         &self,
         work: &[T],
@@ -26,23 +26,21 @@ impl Pairs<'_> {
     ) {
         let [freedoms, size] = self.places.sizes;
         let wide = 2 * (freedoms + size);
-        let (room, more) = room.split_at_mut(super::room_to_solve(size));
+        let (room, more) = room.split_at_mut(super::room_to_solve(size, freedoms));
         let (needed, more) = more.split_at_mut(size * width);
-        let (solved, more) = more.split_at_mut(size * freedoms);
         let (sums, bends) = more.split_at_mut(width);
-        bends.fill(T::zero());
         self.fill_bends(work, bends, wide);
-        needed.fill(T::zero());
         self.fill_slopes(work, needed, width, |entry| entry);
-        let (mut factors, strip) = self.split(room);
+        let (mut factors, mut sides) = self.split(room, freedoms);
         self.fill_mass(work, factors.entries, factors.stride);
         self.factorise(&mut factors);
         for speed in 0..size {
             for k in 0..freedoms {
-                solved[speed * freedoms + k] = bends[k * wide + freedoms + size + speed];
+                let place = speed * sides.stride + k;
+                sides.entries[place] = bends[k * wide + freedoms + size + speed];
             }
         }
-        self.solve(&factors, strip, solved, freedoms);
+        self.solve(&factors, &mut sides);
         // Efforts stand behind v̄̇ among what bends.
         let place = |x: usize| if x < freedoms + size { x } else { x + size };
         for (i, row) in rows.chunks_exact_mut(width.max(1)).enumerate() {
@@ -53,7 +51,7 @@ impl Pairs<'_> {
         for k in 0..freedoms {
             sums.fill(T::zero());
             for speed in 0..size {
-                let factor = solved[speed * freedoms + k];
+                let factor = sides.entries[speed * sides.stride + k];
                 let row = &needed[speed * width..][..width];
                 for (sum, &entry) in sums.iter_mut().zip(row) {
                     *sum = factor.mul_add(entry, *sum);

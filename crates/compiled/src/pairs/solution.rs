@@ -15,48 +15,83 @@ pub(super) struct Factors<'a, T> {
     pub(super) stride: usize,
 }
 
+/// Right-hand sides, then what they are solved to, by rows.
+pub(super) struct RightHandSides<'a, T> {
+    pub(super) entries: &'a mut [T],
+    /// Numbers of a row: blocks of columns end within it.
+    pub(super) stride: usize,
+}
+
 /// Columns that are solved for at once, at most: what registers hold.
 const STRIP: usize = 48;
 /// Columns of the smallest block.
 const BLOCK: usize = 8;
 
-/// Numbers of a row of M̄ as it is factorised.
-const fn stride(size: usize) -> usize {
-    size.next_multiple_of(BLOCK)
+/// Numbers of a row of so many columns.
+const fn stride(columns: usize) -> usize {
+    columns.next_multiple_of(BLOCK)
 }
 
-/// Numbers that solving with M̄ of so many speeds needs room for.
+/// Numbers that solving with M̄ of so many speeds needs room for, with so many columns of right-hand sides.
 #[must_use]
-pub const fn room_to_solve(size: usize) -> usize {
-    size * (stride(size) + STRIP)
+pub const fn room_to_solve(size: usize, columns: usize) -> usize {
+    size * (stride(size) + stride(columns))
+}
+
+/// Calls a function with the number of columns of a strip as a constant.
+macro_rules! with_columns {
+    ($count:expr, $call:ident($($argument:expr),*)) => {
+        match $count {
+            0 => {}
+            41.. => Self::$call::<T, STRIP>($($argument),*),
+            33.. => Self::$call::<T, 40>($($argument),*),
+            25.. => Self::$call::<T, 32>($($argument),*),
+            17.. => Self::$call::<T, 24>($($argument),*),
+            9.. => Self::$call::<T, 16>($($argument),*),
+            _ => Self::$call::<T, BLOCK>($($argument),*),
+        }
+    };
 }
 
 impl Pairs<'_> {
-    /// Room for M̄, and for the columns that are solved for.
-    pub(super) fn split<'r, T: Scalar>(&self, room: &'r mut [T]) -> (Factors<'r, T>, &'r mut [T]) {
-        let stride = stride(self.size());
-        let (entries, strip) = room.split_at_mut(self.size() * stride);
-        (Factors { entries, stride }, strip)
+    /// Room for M̄, and for so many columns that are solved for.
+    pub(super) fn split<'r, T: Scalar>(
+        &self,
+        room: &'r mut [T],
+        columns: usize,
+    ) -> (Factors<'r, T>, RightHandSides<'r, T>) {
+        let (size, [own, other]) = (self.size(), [self.size(), columns].map(stride));
+        let (entries, sides) = room.split_at_mut(size * own);
+        let factors = Factors {
+            entries,
+            stride: own,
+        };
+        let sides = RightHandSides {
+            entries: &mut sides[..size * other],
+            stride: other,
+        };
+        (factors, sides)
     }
 
-    /// Makes given rates known: what they take of others moves to the right-hand side.
+    /// Makes given rates known: what they take of others moves to the right-hand side. They stand in the column `rates`.
     pub(super) fn hold<T: Scalar>(
         &self,
         matrix: &mut Factors<'_, T>,
-        rows: &mut [T],
-        width: usize,
+        sides: &mut RightHandSides<'_, T>,
+        rates: usize,
     ) {
+        let width = sides.stride;
         for &[speed, column] in self.held {
             for row in 0..self.size() {
                 let place = row.max(speed) * matrix.stride + row.min(speed);
-                rows[row * width + column] = -matrix.entries[place];
+                sides.entries[row * width + column] = -matrix.entries[place];
             }
         }
         for &[speed, _] in self.held {
-            rows[speed * width..][..width - 1].fill(T::zero());
+            sides.entries[speed * width..][..rates].fill(T::zero());
         }
         for &[speed, column] in self.held {
-            rows[speed * width + column] = T::one();
+            sides.entries[speed * width + column] = T::one();
         }
         self.fix(matrix);
     }
@@ -77,14 +112,9 @@ impl Pairs<'_> {
     pub(super) fn factorise<T: Scalar>(&self, matrix: &mut Factors<'_, T>) {
         let stride = matrix.stride;
         for i in (0..self.size()).rev() {
-            let end = (i + 1).next_multiple_of(BLOCK);
-            let mut from = 0;
-            while from < end {
-                from += match end - from {
-                    32.. => self.eliminate::<T, 32>(matrix, i, from),
-                    16.. => self.eliminate::<T, 16>(matrix, i, from),
-                    _ => self.eliminate::<T, BLOCK>(matrix, i, from),
-                };
+            let end = self::stride(i + 1);
+            for from in (0..end).step_by(STRIP) {
+                with_columns!(end - from, eliminate(self.below[i], matrix, i, from));
             }
             let pivot = &mut matrix.entries[i * stride + i];
             *pivot = T::one() / *pivot;
@@ -99,149 +129,163 @@ impl Pairs<'_> {
         }
     }
 
-    /// Takes those below a row from its block of columns; how many these are.
-    #[inline(always)]
+    /// Takes those below a row from its block of columns.
+    ///
+    /// Functions of one row are not inlined: each has the registers for itself.
+    #[inline(never)]
     fn eliminate<T: Scalar, const N: usize>(
-        &self,
+        below: &[[usize; 2]],
         matrix: &mut Factors<'_, T>,
         row: usize,
         from: usize,
-    ) -> usize {
-        let Factors { entries, stride } = matrix;
-        let place = row * *stride + from;
-        let mut own: [T; N] = *super::numbers(entries, place);
-        for &[first, last] in self.below[row] {
-            for k in (first..last).rev() {
-                let below = k * *stride;
-                let factor = entries[below + row] * entries[below + k];
-                less(&mut own, factor, super::numbers(entries, below + from));
+    ) {
+        let stride = matrix.stride;
+        let (own_rows, others) = matrix.entries.split_at_mut((row + 1) * stride);
+        let place = row * stride + from;
+        let mut own: [T; N] = *super::numbers(own_rows, place);
+        for &[first, last] in below {
+            let others = &others[(first - row - 1) * stride..(last - row - 1) * stride];
+            for (k, other) in (first..last).zip(others.chunks_exact(stride)).rev() {
+                let factor = other[row] * other[k];
+                less(&mut own, factor, super::numbers(other, from));
             }
         }
-        entries[place..][..N].copy_from_slice(&own);
-        N
+        own_rows[place..][..N].copy_from_slice(&own);
     }
 
     /// `M̄⁻¹` times the columns of the tables, as many at once as registers take.
     pub(super) fn solve<T: Scalar>(
         &self,
         factors: &Factors<'_, T>,
-        strip: &mut [T],
-        rows: &mut [T],
-        width: usize,
+        sides: &mut RightHandSides<'_, T>,
     ) {
+        let mut done = 0;
         for &[from, to] in self.columns {
+            let (from, to) = (done.max(from / BLOCK * BLOCK), stride(to));
+            done = to.max(done);
             // Strips as wide as each other: a narrow one takes nearly as long as a wide one.
-            let count = (to - from).div_ceil((to - from).div_ceil(STRIP));
-            for from in (from..to).step_by(count) {
-                let columns = (from, count.min(to - from), width);
-                match count {
-                    41.. => self.solve_strip::<T, STRIP>(factors, strip, rows, columns),
-                    33.. => self.solve_strip::<T, 40>(factors, strip, rows, columns),
-                    25.. => self.solve_strip::<T, 32>(factors, strip, rows, columns),
-                    17.. => self.solve_strip::<T, 24>(factors, strip, rows, columns),
-                    9.. => self.solve_strip::<T, 16>(factors, strip, rows, columns),
-                    _ => self.solve_strip::<T, BLOCK>(factors, strip, rows, columns),
-                }
-            }
-        }
-        if let Some(first) = self.mirrored {
-            for row in 0..self.size() {
-                for column in 0..row {
-                    rows[row * width + first + column] = rows[column * width + first + row];
-                }
+            let strips = to.saturating_sub(from).div_ceil(STRIP).max(1);
+            let width = stride(to.saturating_sub(from).div_ceil(strips)).max(BLOCK);
+            for from in (from..to).step_by(width) {
+                self.solve_strip(factors, sides, [from, to.min(from + width)]);
             }
         }
     }
 
-    /// The same of `count` columns beside each other, at most N.
-    #[inline(always)]
-    fn solve_strip<T: Scalar, const N: usize>(
+    /// The same of columns beside each other.
+    ///
+    /// A column of M̄⁻¹ is a unit below its diagonal, and not wanted there: rows begin at the block of the diagonal.
+    fn solve_strip<T: Scalar>(
         &self,
         factors: &Factors<'_, T>,
-        strip: &mut [T],
-        rows: &mut [T],
-        (from, count, width): (usize, usize, usize),
+        sides: &mut RightHandSides<'_, T>,
+        [from, to]: [usize; 2],
     ) {
-        // A column of M̄⁻¹ is a unit below its diagonal, and not wanted there.
-        let wanted = self
-            .mirrored
-            .and_then(|first| (from + count).checked_sub(first));
-        let wanted = wanted
-            .filter(|&wanted| wanted > 0)
-            .map_or(self.size(), |wanted| wanted.min(self.size()));
-        let strip = &mut strip.as_chunks_mut::<N>().0[..wanted];
-        for (i, own) in strip.iter_mut().enumerate() {
-            *own = load(&rows[i * width + from..]);
+        let mirrored = self.mirrored.filter(|&first| first <= from);
+        let start = |row| mirrored.map_or(from, |first| from.max((first + row) / BLOCK * BLOCK));
+        let end = mirrored.map_or(self.size(), |first| self.size().min(to - first));
+        for i in (0..end).rev() {
+            let place = (i, start(i));
+            with_columns!(
+                to - start(i),
+                solve_up(self.below[i], factors, sides, place, end)
+            );
         }
-        self.solve_up(factors, strip);
-        self.solve_down(factors, strip);
-        for (k, own) in strip.iter().enumerate() {
-            store(&mut rows[k * width + from..], own, count);
+        for k in 0..end {
+            let place = (k, start(k));
+            with_columns!(
+                to - start(k),
+                solve_down(self.above[k], factors, sides, place)
+            );
         }
     }
 
-    /// From the leaves to the root.
-    #[inline(always)]
-    fn solve_up<T: Scalar, const N: usize>(&self, factors: &Factors<'_, T>, strip: &mut [[T; N]]) {
-        for i in (0..strip.len()).rev() {
-            let mut own = strip[i];
-            for &[from, to] in self.below[i] {
-                for k in (from..to.min(strip.len())).rev() {
-                    less(&mut own, factors.entries[k * factors.stride + i], &strip[k]);
-                }
+    /// From the leaves to the root: takes the rows below from one of them, from a column on.
+    #[inline(never)]
+    fn solve_up<T: Scalar, const N: usize>(
+        below: &[[usize; 2]],
+        factors: &Factors<'_, T>,
+        sides: &mut RightHandSides<'_, T>,
+        (row, column): (usize, usize),
+        end: usize,
+    ) {
+        let mut own: [T; N] = *super::numbers(sides.row(row), column);
+        for &[from, to] in below {
+            let to = to.min(end).max(from);
+            let factors = factors.entries[from * factors.stride..to * factors.stride]
+                .chunks_exact(factors.stride);
+            for (factors, other) in factors.zip(sides.rows(from, to)).rev() {
+                less(&mut own, factors[row], super::numbers(other, column));
             }
-            strip[i] = own;
         }
+        sides.assign(row, column, &own);
     }
 
     /// From the root to the leaves.
-    #[inline(always)]
+    #[inline(never)]
     fn solve_down<T: Scalar, const N: usize>(
-        &self,
+        above: &[[usize; 2]],
         factors: &Factors<'_, T>,
-        strip: &mut [[T; N]],
+        sides: &mut RightHandSides<'_, T>,
+        (row, column): (usize, usize),
     ) {
-        for k in 0..strip.len() {
-            let row = &factors.entries[k * factors.stride..][..factors.stride];
-            let mut own = strip[k];
-            for entry in &mut own {
-                *entry *= row[k];
+        let factors = &factors.entries[row * factors.stride..][..factors.stride];
+        let mut own: [T; N] = *super::numbers(sides.row(row), column);
+        for entry in &mut own {
+            *entry *= factors[row];
+        }
+        for &[from, to] in above {
+            for (&factor, other) in factors[from..to].iter().zip(sides.rows(from, to)).rev() {
+                less(&mut own, factor, super::numbers(other, column));
             }
-            for &[from, to] in self.above[k] {
-                for i in (from..to).rev() {
-                    less(&mut own, row[i], &strip[i]);
-                }
+        }
+        sides.assign(row, column, &own);
+    }
+
+    /// Assigns the rows of results, `width` numbers each.
+    pub(super) fn finish<T: Scalar>(
+        &self,
+        sides: &RightHandSides<'_, T>,
+        rows: &mut [T],
+        width: usize,
+    ) {
+        let width = width.max(1);
+        let solved = || sides.entries.chunks_exact(sides.stride.max(1));
+        for (row, own) in rows.chunks_exact_mut(width).zip(solved()) {
+            let (blocks, rest) = row.as_chunks_mut::<BLOCK>();
+            let (own, _) = own.as_chunks::<BLOCK>();
+            for (block, own) in blocks.iter_mut().zip(own) {
+                *block = *own;
             }
-            strip[k] = own;
+            let left = own.get(blocks.len()).into_iter().flatten();
+            for (place, &entry) in rest.iter_mut().zip(left) {
+                *place = entry;
+            }
+        }
+        let Some(first) = self.mirrored else { return };
+        for (k, own) in solved().enumerate() {
+            let right = &own[first + k + 1..first + self.size()];
+            let below = rows.chunks_exact_mut(width).skip(k + 1);
+            for (row, &entry) in below.zip(right) {
+                row[first + k] = entry;
+            }
         }
     }
 }
 
-/// N entries of a row, or what there is of them and zeros.
-#[inline(always)]
-fn load<T: Scalar, const N: usize>(row: &[T]) -> [T; N] {
-    match row.first_chunk() {
-        Some(row) => *row,
-        None => {
-            let mut all = [T::zero(); N];
-            all[..row.len()].copy_from_slice(row);
-            all
-        }
+impl<T: Scalar> RightHandSides<'_, T> {
+    fn row(&self, row: usize) -> &[T] {
+        &self.entries[row * self.stride..][..self.stride]
     }
-}
 
-/// Assigns the first `count` entries of a row.
-#[inline(always)]
-fn store<T: Scalar>(row: &mut [T], entries: &[T], count: usize) {
-    let (row, _) = row.split_at_mut(count);
-    let (blocks, rest) = row.as_chunks_mut::<BLOCK>();
-    let (full, others) = entries.as_chunks::<BLOCK>();
-    for (block, entries) in blocks.iter_mut().zip(full) {
-        *block = *entries;
+    /// Rows, from the first to behind the last.
+    fn rows(&self, from: usize, to: usize) -> core::slice::ChunksExact<'_, T> {
+        self.entries[from * self.stride..to * self.stride].chunks_exact(self.stride)
     }
-    let left = full.get(blocks.len()).map_or(others, |block| &block[..]);
-    for (place, &entry) in rest.iter_mut().zip(left) {
-        *place = entry;
+
+    /// Assigns columns beside each other of a row.
+    fn assign<const N: usize>(&mut self, row: usize, column: usize, block: &[T; N]) {
+        self.entries[row * self.stride + column..][..N].copy_from_slice(block);
     }
 }
 

@@ -77,8 +77,7 @@ impl<'a> Layout<'a> {
         self.others(entries);
         let followed = rates.map(|rates| self.tree.followed_variations(rates));
         for (column, row, value) in followed.into_iter().flatten() {
-            self.tables.followed.push([row, column, self.work.len()]);
-            self.work.push(value.settled());
+            self.followed([row, column], value);
         }
     }
 
@@ -138,7 +137,7 @@ impl<'a> Layout<'a> {
                 self.efforts(index);
             }
             for (row, rates) in own.filter_map(|row| Some((row, rates?))) {
-                self.entry([row, self.tables.size[1] - 1], rates[row]);
+                self.followed([row, self.tables.size[1] - 1], rates[row]);
             }
             self.bends(index, entries[2]);
         }
@@ -233,6 +232,12 @@ impl<'a> Layout<'a> {
             self.tables.entries.push([row, column, self.work.len()]);
             self.work.push(value.settled());
         }
+    }
+
+    /// An entry that is added to what is solved.
+    fn followed(&mut self, [row, column]: [usize; 2], value: Sym) {
+        self.tables.followed.push([row, column, self.work.len()]);
+        self.work.push(value.settled());
     }
 
     /// An entry of M̄ and its mirror image.
@@ -357,7 +362,7 @@ impl<'a> Layout<'a> {
                 self.tables.columns = spans(&self.filled(), self.tables.mirrored);
             }
         }
-        if self.tables.room(1) > 0 {
+        if self.tables.solved_columns().is_some() {
             self.tables.below = self.below();
         }
         (self.work, self.tables)

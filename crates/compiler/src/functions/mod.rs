@@ -14,7 +14,6 @@ use super::model::Model;
 use super::packs::{self, Packs};
 use super::pairs::Tables;
 use super::prune::{Link, Pruning, prune};
-use hamel_compiled::room_in_lanes;
 
 impl Kind {
     /// The recursions that compute it.
@@ -346,9 +345,10 @@ pub fn compile_in_lanes(model: &Model, kind: Kind, pairs: bool) -> Result<Functi
 /// Numbers that a function in lanes has in memory for each state: arguments and results, and for loops over pairs those of the bodies and the factors of M̄.
 fn numbers_in_lanes(function: &Function) -> usize {
     let arguments: usize = function.arguments.iter().map(|(_, size)| size).sum();
-    let of_pairs = function.pairs.as_ref().map_or(0, |tables| {
-        function.outputs.len() + tables.room(room_in_lanes(tables.above.len()))
-    });
+    let of_pairs = function
+        .pairs
+        .as_ref()
+        .map_or(0, |tables| function.outputs.len() + tables.room_of_lanes());
     arguments + function.results() + of_pairs
 }
 

@@ -73,11 +73,21 @@ impl Written {
             size: tables.above.len(),
             width: tables.size[1],
             places: places(&tables.places),
-            room: tables.room(tables.above.len().pow(2)),
+            room: room(tables),
             is_wide: !matches!(tables.product, Product::Mass | Product::InverseMass),
             mirrored: optional(tables.mirrored).to_string(),
             tables: all.into_iter().map(Table::new).collect(),
         }
+    }
+}
+
+/// Numbers that loops need room for: M̄, and what is solved where this is no part of the results.
+fn room(tables: &Tables) -> usize {
+    let size = tables.above.len();
+    match (tables.solved_columns(), tables.product) {
+        (None, _) => 0,
+        (Some(columns), Product::SecondForward) => tables.room(size * (size + columns)),
+        (Some(_), _) => tables.room(size * size),
     }
 }
 

@@ -1,6 +1,6 @@
 //! The constant of a module by which the runtime finds its functions.
 
-use super::lanes;
+use super::{into, lanes};
 use crate::emit::Function;
 use crate::functions::Kind;
 use crate::model::Model;
@@ -78,18 +78,19 @@ fn one_state(function: &Function) -> TokenStream {
 
 /// The same with results in rows, one after the other.
 fn rows_of_state(function: &Function) -> TokenStream {
-    let name = Ident::new(function.name, Span::call_site());
-    let count = Literal::usize_unsuffixed(function.results());
-    let entries = match function.columns {
-        None => quote! { as_slice },
-        Some(_) => quote! { as_flattened },
-    };
+    if function.columns.is_none() {
+        return one_state(function);
+    }
+    let into = into(function);
     quote! {
         |q, v, u, results| {
-            if let (Some(q), Some(v), Some(u), Some(results)) =
-                (q.first_chunk(), v.first_chunk(), u.first_chunk(), results.get_mut(..#count))
-            {
-                results.copy_from_slice(#name::<f64>(q, v, u).#entries());
+            if let (Some(q), Some(v), Some(u), Some(rows)) = (
+                q.first_chunk(),
+                v.first_chunk(),
+                u.first_chunk(),
+                results.as_chunks_mut().0.first_chunk_mut(),
+            ) {
+                #into::<f64>(q, v, u, rows);
             }
         }
     }
@@ -97,18 +98,17 @@ fn rows_of_state(function: &Function) -> TokenStream {
 
 /// The same with weights λ.
 fn rows_of_weights(function: &Function) -> TokenStream {
-    let name = Ident::new(function.name, Span::call_site());
-    let count = Literal::usize_unsuffixed(function.results());
+    let into = into(function);
     quote! {
         |q, v, u, lambda, results| {
-            if let (Some(q), Some(v), Some(u), Some(lambda), Some(results)) = (
+            if let (Some(q), Some(v), Some(u), Some(lambda), Some(rows)) = (
                 q.first_chunk(),
                 v.first_chunk(),
                 u.first_chunk(),
                 lambda.first_chunk(),
-                results.get_mut(..#count),
+                results.as_chunks_mut().0.first_chunk_mut(),
             ) {
-                results.copy_from_slice(#name::<f64>(q, v, u, lambda).as_flattened());
+                #into::<f64>(q, v, u, lambda, rows);
             }
         }
     }
@@ -116,12 +116,13 @@ fn rows_of_weights(function: &Function) -> TokenStream {
 
 /// The same of Q alone.
 fn rows_of_configuration(function: &Function) -> TokenStream {
-    let name = Ident::new(function.name, Span::call_site());
-    let count = Literal::usize_unsuffixed(function.results());
+    let into = into(function);
     quote! {
         |q, _, _, results| {
-            if let (Some(q), Some(results)) = (q.first_chunk(), results.get_mut(..#count)) {
-                results.copy_from_slice(#name::<f64>(q).as_flattened());
+            if let (Some(q), Some(rows)) =
+                (q.first_chunk(), results.as_chunks_mut().0.first_chunk_mut())
+            {
+                #into::<f64>(q, rows);
             }
         }
     }

@@ -105,10 +105,6 @@ fn sizes_are_all_positive(model: &Model) -> bool {
 
 fn item(function: &Function, bodies: &[String]) -> TokenStream {
     let lowered = Lowered::with_packs(function, bodies, &RESERVED);
-    let four = function
-        .packs
-        .is_some()
-        .then(|| quote! { let four = <T::Four>::from_array; });
     let name = Ident::new(function.name, Span::call_site());
     let arguments = function.arguments.iter().map(|&(argument, size)| {
         let (name, size) = (
@@ -117,6 +113,60 @@ fn item(function: &Function, bodies: &[String]) -> TokenStream {
         );
         quote! { #name: &[T; #size] }
     });
+    let arguments: Vec<TokenStream> = arguments.collect();
+    let docs = docs(function);
+    let head = quote! {
+        #(#[doc = #docs])*
+        #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
+    };
+    let body = body(function, &lowered);
+    let count = |number: usize| Literal::usize_unsuffixed(number);
+    let Some(columns) = function.columns else {
+        let size = count(function.results());
+        return quote! {
+            #head
+            #[must_use]
+            pub fn #name<T: Scalar>(#(#arguments),*) -> [T; #size] { #body }
+        };
+    };
+    // Rows are long: they are assigned where they are wanted.
+    let (width, size) = (count(columns), count(function.results() / columns));
+    let names = function.arguments.iter();
+    let names = names.map(|(argument, _)| format_ident!("{}", argument.name()));
+    let into = into(function);
+    let returned = format!(" Returns what [`{into}`] assigns.");
+    quote! {
+        #head
+        pub fn #into<T: Scalar>(#(#arguments,)* rows: &mut [[T; #width]; #size]) { #body }
+
+        #[doc = #returned]
+        #[must_use]
+        pub fn #name<T: Scalar>(#(#arguments),*) -> [[T; #width]; #size] {
+            let mut rows = [[T::zero(); #width]; #size];
+            #into(#(#names,)* &mut rows);
+            rows
+        }
+    }
+}
+
+fn docs(function: &Function) -> Vec<String> {
+    let side_by_side = match function.packs {
+        Some(_) => "; those of like limbs are side by side",
+        None => "",
+    };
+    vec![
+        format!(" {}", function.summary),
+        String::new(),
+        format!(" Operations: {}{side_by_side}.", function.operations()),
+    ]
+}
+
+/// What a function does: assigns `rows` where it has columns, and ends with its results where it has none.
+fn body(function: &Function, lowered: &Lowered) -> TokenStream {
+    let four = function
+        .packs
+        .is_some()
+        .then(|| quote! { let four = <T::Four>::from_array; });
     let lines = lowered.lines.iter().map(line);
     let arrays = lowered.arrays.iter().map(|(&width, &rows)| {
         let (name, width, rows) = (
@@ -126,13 +176,6 @@ fn item(function: &Function, bodies: &[String]) -> TokenStream {
         );
         quote! { let mut #name = [[n(0.0); #width]; #rows]; }
     });
-    let columns = function.columns.unwrap_or(1);
-    let size = Literal::usize_unsuffixed(function.results() / columns);
-    let width = Literal::usize_unsuffixed(columns);
-    let kind = match function.columns {
-        None => quote! { [T; #size] },
-        Some(_) => quote! { [[T; #width]; #size] },
-    };
     let entries = Literal::usize_unsuffixed(function.outputs.len());
     let results = match &lowered.outputs {
         None => quote! { let mut results = [n(0.0); #entries]; },
@@ -149,35 +192,24 @@ fn item(function: &Function, bodies: &[String]) -> TokenStream {
             quote! { #work #rows }
         }
         (None, None) => quote! { results },
-        (None, Some(_)) => quote! {
-            core::array::from_fn(|i| core::array::from_fn(|j| results[#width * i + j]))
-        },
+        (None, Some(_)) => quote! { rows.as_flattened_mut().copy_from_slice(&results); },
         (Some(outputs), None) => quote! { [#(#outputs),*] },
-        (Some(outputs), Some(_)) => {
+        (Some(outputs), Some(columns)) => {
             let rows = outputs.chunks(columns).map(|row| quote! { [#(#row),*] });
-            quote! { [#(#rows),*] }
+            quote! { *rows = [#(#rows),*]; }
         }
     };
-    let side_by_side = match function.packs {
-        Some(_) => "; those of like limbs are side by side",
-        None => "",
-    };
-    let docs = [
-        format!(" {}", function.summary),
-        String::new(),
-        format!(" Operations: {}{side_by_side}.", function.operations()),
-    ];
     quote! {
-        #(#[doc = #docs])*
-        #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
-        #[must_use]
-        pub fn #name<T: Scalar>(#(#arguments),*) -> #kind {
-            let n = T::from_f64;
-            #four
-            #(#arrays)*
-            #results
-            #(#lines)*
-            #result
-        }
+        let n = T::from_f64;
+        #four
+        #(#arrays)*
+        #results
+        #(#lines)*
+        #result
     }
+}
+
+/// The name of a function that assigns its rows instead of returning them.
+fn into(function: &Function) -> Ident {
+    format_ident!("{}_into", function.name)
 }

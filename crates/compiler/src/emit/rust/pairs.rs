@@ -2,21 +2,22 @@
 
 use crate::pairs::{Product, Tables};
 use hamel_codegen::emit::rust::comment;
-use hamel_compiled::{Carrying, Meeting, Pairing, Places, room_in_lanes, room_to_solve};
+use hamel_compiled::{Carrying, Meeting, Pairing, Places};
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
-/// The rows of a function, made of the numbers in `results`.
+/// Assigns the rows of a function, made of the numbers in `results`.
 pub fn rows(tables: &Tables) -> TokenStream {
-    let [rows, width] = tables.size.map(Literal::usize_unsuffixed);
+    let width = Literal::usize_unsuffixed(tables.size[1]);
     let method = format_ident!("{}", tables.product.name());
-    let room = tables.room(room_to_solve(tables.above.len()));
-    let room = Literal::usize_unsuffixed(room);
+    let room = Literal::usize_unsuffixed(tables.room_of_one());
     let room = quote! { let mut room = ::hamel::compiled::Aligned([n(0.0); #room]); };
+    let zeros = quote! { rows.as_flattened_mut().fill(n(0.0)); };
     let call = match tables.product {
-        Product::Mass | Product::Inverse => {
-            quote! { PAIRS.#method(&results, rows.as_flattened_mut()); }
-        }
+        Product::Mass | Product::Inverse => quote! {
+            #zeros
+            PAIRS.#method(&results, rows.as_flattened_mut());
+        },
         Product::InverseMass => quote! {
             #room
             PAIRS.#method(&results, &mut room.0, rows.as_flattened_mut());
@@ -25,18 +26,17 @@ pub fn rows(tables: &Tables) -> TokenStream {
             #room
             PAIRS.#method(&results, &mut room.0, rows.as_flattened_mut(), #width);
         },
-        Product::SecondInverse => {
-            quote! { PAIRS.#method(&results, rows.as_flattened_mut(), #width); }
-        }
+        Product::SecondInverse => quote! {
+            #zeros
+            PAIRS.#method(&results, rows.as_flattened_mut(), #width);
+        },
     };
     let constants = constants(tables);
     let heading = comment("each pair of joints on one way to the root:");
     quote! {
         #heading
         #constants
-        let mut rows = [[n(0.0); #width]; #rows];
         #call
-        rows
     }
 }
 
@@ -45,7 +45,7 @@ pub fn rows_in_lanes(tables: &Tables, numbers: usize) -> TokenStream {
     let constants = constants(tables);
     let strips = strips(tables, numbers);
     let width = Literal::usize_unsuffixed(tables.size[1]);
-    let room = Literal::usize_unsuffixed(tables.room(room_in_lanes(tables.above.len())));
+    let room = Literal::usize_unsuffixed(tables.room_of_lanes());
     let room = quote! {
         const STRIPS: &[::hamel::compiled::Strip<'static>] = &[#(#strips),*];
         let mut room = [::hamel::compiled::Lanes([0.0; ::hamel::compiled::LANES]); #room];
