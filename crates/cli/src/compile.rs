@@ -78,22 +78,28 @@ impl Args {
     }
 }
 
-/// A function that can be written.
+/// A function that can be written; with underscores it is called so in what is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum FunctionName {
     /// Accelerations from Q, v̄ and τ
+    #[value(alias = "forward_dynamics")]
     ForwardDynamics,
     /// Efforts from Q, v̄ and accelerations
+    #[value(alias = "inverse_dynamics")]
     InverseDynamics,
     /// M̄(Q)
+    #[value(alias = "mass_matrix")]
     MassMatrix,
     /// Efforts at zero acceleration
+    #[value(alias = "bias_forces")]
     BiasForces,
     /// v̄ and p̄̇ from Q, p̄ and τ
+    #[value(alias = "momentum_rates")]
     MomentumRates,
     /// p̄ from Q and v̄
     Momenta,
     /// v̄ from Q and p̄
+    #[value(alias = "speeds_from_momenta")]
     SpeedsFromMomenta,
     /// H from Q and p̄
     Hamiltonian,
@@ -102,14 +108,19 @@ pub enum FunctionName {
     /// Where the bodies are
     Poses,
     /// How accelerations change with local coordinates, v̄ and τ
+    #[value(alias = "forward_dynamics_derivatives")]
     ForwardDynamicsDerivatives,
     /// How efforts change with local coordinates and v̄
+    #[value(alias = "inverse_dynamics_derivatives")]
     InverseDynamicsDerivatives,
     /// M̄⁻¹(Q)
+    #[value(alias = "inverse_mass_matrix")]
     InverseMassMatrix,
     /// Second derivatives of accelerations, contracted with weights
+    #[value(alias = "forward_dynamics_second_derivatives")]
     ForwardDynamicsSecondDerivatives,
     /// Second derivatives of efforts, contracted with weights
+    #[value(alias = "inverse_dynamics_second_derivatives")]
     InverseDynamicsSecondDerivatives,
 }
 

@@ -40,6 +40,17 @@ fn a_module_in_c_is_a_source_and_a_header_under_the_name_of_the_file() {
     assert!(header.contains("body `front`"), "{header}");
 }
 
+/// Functions are asked for by the names that they have in modules, or with hyphens as all options have.
+#[test]
+fn functions_are_called_as_in_modules_or_with_hyphens() {
+    let written = |name: &str| stdout(&["compile", "scenes/snakeboard.toml", "--function", name]);
+    for name in ["momentum_rates", "speeds_from_momenta", "mass_matrix"] {
+        let module = written(name);
+        assert!(module.contains(&format!("pub fn {name}<")), "{module}");
+        assert_eq!(written(&name.replace('_', "-")), module);
+    }
+}
+
 /// Who calls the functions needs nothing but the header.
 #[test]
 fn a_header_tells_units_axes_and_order_of_all_entries() {

@@ -1,6 +1,7 @@
 //! Why a function is not written.
 
-use super::{Kind, LONGEST, LONGEST_IN_LANES, WIDEST_IN_LANES};
+use super::in_lanes::{LONGEST_IN_LANES, WIDEST_IN_LANES};
+use super::{Kind, LONGEST};
 
 /// A function that would be too long.
 #[derive(Clone, Debug, PartialEq, Eq)]
