@@ -472,6 +472,19 @@ fn the_error_of_a_motion_is_told_unless_it_is_not_wanted() {
     );
 }
 
+/// Inputs that bend or stand still between instants need a finer motion to compare with, and a neighbour of it: both took twice to ten times as many evaluations as the motion.
+#[test]
+fn estimates_beside_controllers_take_few_times_as_much_as_the_motion() {
+    for (scene, most) in [("snakeboard", 1.5), ("ball_pendulum_swing_up", 3.5)] {
+        let scene = format!("scenes/{scene}.toml");
+        let text = stdout(&["simulate", &scene, "--json"]);
+        let report: Value = serde_json::from_str(&text).expect("JSON and nothing else");
+        let count = |part: &Value| part["evaluations"].as_f64().expect("they are counted");
+        let ratio = count(&report["error"]) / count(&report["statistics"]);
+        assert!(ratio < most, "{scene}: {ratio}");
+    }
+}
+
 /// Where friction of 10⁴ N s/m brakes a cart at a rate of 10⁴ 1/s, stability limits the steps of an explicit method at all tolerances.
 const BRAKED: &str = r#"hamel = 1
 name = "braked"

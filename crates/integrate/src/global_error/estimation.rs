@@ -33,6 +33,9 @@ const FEW_ERRORS: f64 = 2.0;
 /// How many times finer that is, in the tolerance, or in the step.
 const FINER: (f64, f64) = (100.0, 5.0);
 
+/// Motions of more steps are compared with one whose error is this many times smaller: what is left of it in the estimate is an eighth, and it takes little more than the motion.
+const MORE_ACCURATE: f64 = 8.0;
+
 /// Below this, errors of the exponential method may be those of rounding in oscillations that its steps pass over.
 pub(super) const OSCILLATIONS: f64 = 1e-11;
 
@@ -218,7 +221,7 @@ impl<'a, 'r> Estimation<'a, 'r> {
         let (first, second) = self.coarser();
         let steps = self.solution.statistics.steps as f64;
         let fine = self.companion(first, times)?;
-        let coarse = self.companion_from(second, times, self.initial)?;
+        let coarse = self.companion_from(second, times, (self.initial, f64::INFINITY))?;
         let order = f64::from(self.order());
         let [near, far] =
             [&fine, &coarse].map(|companion| beside(&self.distances(&companion.states, times)));
@@ -335,16 +338,24 @@ impl<'a, 'r> Estimation<'a, 'r> {
             Method::Fixed { scheme, dt } => Method::fixed(scheme, dt / FINER.1),
             Method::Controlled { scheme, control } => Method::Controlled {
                 scheme,
-                control: StepControl {
-                    tolerance: (control.tolerance / FINER.0).max(StepControl::LEAST_TOLERANCE),
-                    max_step: control.max_step.min(0.5 * self.mean_step()),
-                    ..control
-                },
+                control: self.finer(control),
             },
         };
         let fine = self.companion(method, times)?;
         let from_steps = self.distances(&fine.states, times);
         Ok(self.with_rounding(from_steps, [(self.options.method, &fine); 2], times))
+    }
+
+    /// Smaller tolerances, and steps that are shorter where these do not decide.
+    fn finer(&self, control: StepControl) -> StepControl {
+        let is_short = self.solution.statistics.steps < FEW;
+        let more = if is_short { FINER.0 } else { MORE_ACCURATE };
+        let shorter = Float::powf(more, -1.0 / f64::from(self.order()));
+        StepControl {
+            tolerance: (control.tolerance / more).max(StepControl::LEAST_TOLERANCE),
+            max_step: control.max_step.min(shorter * self.mean_step()),
+            ..control
+        }
     }
 
     fn mean_step(&self) -> f64 {
@@ -376,16 +387,17 @@ impl<'a, 'r> Estimation<'a, 'r> {
 
     /// The motion by another method. Where it goes through other pieces, the distance from it tells little.
     fn companion(&mut self, method: Method, times: &[State]) -> Result<Companion, Doubt> {
-        let companion = self.companion_from(method, times, self.initial)?;
+        let companion = self.companion_from(method, times, (self.initial, f64::INFINITY))?;
         self.compare_pieces(&companion.pieces);
         Ok(companion)
     }
 
+    /// The motion from a state by another method. It has fewer states than there are times where it would take more steps than `most`.
     pub(super) fn companion_from(
         &mut self,
         method: Method,
         times: &[State],
-        from: &State,
+        (from, most): (&State, f64),
     ) -> Result<Companion, Doubt> {
         let options = Options {
             method,
@@ -400,11 +412,15 @@ impl<'a, 'r> Estimation<'a, 'r> {
             if step.sample.is_some() {
                 paths.push(path.length);
             }
-            ControlFlow::Continue(())
+            match (step.number as f64) < most {
+                true => ControlFlow::Continue(()),
+                false => ControlFlow::Break(()),
+            }
         });
         let solution = solution.map_err(Doubt::Companion)?;
         self.evaluations += solution.statistics.evaluations;
-        if solution.samples.len() < times.len() || paths.len() < times.len() {
+        let is_whole = (solution.statistics.steps as f64) < most;
+        if is_whole && (solution.samples.len() < times.len() || paths.len() < times.len()) {
             return Err(Doubt::Companion("it was ended before".into()));
         }
         Ok(Companion {

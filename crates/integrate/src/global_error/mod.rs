@@ -6,7 +6,7 @@
 //! The companions together take about as many evaluations as the motion.
 //!
 //! Coarser companions tell nothing where the tolerance decides the length of few steps, as where inputs are held or joints stick, and little of methods of high order where something
-//! bends. Such motions are compared with a finer one, which takes one and a half to three times as many evaluations as they do.
+//! bends. Such motions are compared with one of an eighth of their error, which takes up to one and a half times as many evaluations as they do, and so does a neighbour.
 
 mod accelerations;
 mod companion;

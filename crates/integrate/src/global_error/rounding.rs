@@ -15,6 +15,12 @@ const FAR_ABOVE_ROUNDING: f64 = 1e-9;
 /// Neighbours at this distance are too far apart to tell how those go apart that are near.
 const APART: f64 = 0.1;
 
+/// A neighbour that takes this many times as many steps as the motion beside it goes elsewhere: it is followed no farther.
+const STEPS_OF_NEIGHBOURS: f64 = 1.5;
+
+/// So many steps more cost nothing.
+const FEW_STEPS: f64 = 100.0;
+
 /// Bodies that are farther away than this, m, have roundings of positions that are larger than those of speeds.
 const FAR: f64 = 1e3;
 
@@ -102,11 +108,11 @@ impl Estimation<'_, '_> {
         times: &[State],
     ) -> (Option<f64>, Vec<f64>) {
         let (change, least) = (change_of(coarse.0), change_of(fine.0));
-        let found = self.growth((coarse.0, change), &coarse.1.states, times);
+        let found = self.growth((coarse.0, change), coarse.1, times);
         let is_small = |growth: &Vec<f64>| growth.iter().all(|&own| own * change < APART);
         let found = match found {
             Some(growth) if !is_small(&growth) && least < change => {
-                let nearer = self.growth((fine.0, least), &fine.1.states, times);
+                let nearer = self.growth((fine.0, least), fine.1, times);
                 nearer.or(Some(growth))
             }
             found => found,
@@ -115,17 +121,21 @@ impl Estimation<'_, '_> {
         (growth.last().copied(), growth)
     }
 
-    /// How far a neighbour is carried away, as a part of the change of its speeds.
+    /// How far a neighbour of a companion is carried away, as a part of the change of its speeds: as far as ever before where it takes too many steps to be followed.
     fn growth(
         &mut self,
         (method, change): (Method, f64),
-        from: &[State],
+        companion: &Companion,
         times: &[State],
     ) -> Option<Vec<f64>> {
         let moved = self.neighbour(change, times)?;
-        let moved = self.companion_from(method, times, &moved).ok()?;
-        let growth = self.distances(&moved.states, from);
-        Some(growth.iter().map(|distance| distance / change).collect())
+        let most = STEPS_OF_NEIGHBOURS * companion.steps + FEW_STEPS;
+        let moved = (self.companion_from(method, times, (&moved, most))).ok()?;
+        let distances = self.distances(&moved.states, &companion.states);
+        let mut growth: Vec<f64> = distances.iter().map(|distance| distance / change).collect();
+        let largest = growth.iter().copied().fold(1.0, f64::max);
+        growth.resize(times.len(), largest);
+        Some(growth)
     }
 
     /// What half an ulp of the configuration is at each time, where bodies are so far away that it counts: nothing elsewhere, where speeds tell of it. It is seen beside the finer companion: steps of the coarser one
@@ -155,9 +165,10 @@ impl Estimation<'_, '_> {
         let completed = self
             .dynamics
             .complete_speeds(&from.configuration, &mut from.speeds);
-        let found = completed
-            .ok()
-            .and_then(|()| self.companion_from(method, times, &from).ok());
+        let found = completed.ok().and_then(|()| {
+            self.companion_from(method, times, (&from, f64::INFINITY))
+                .ok()
+        });
         let distances = found.map(|found| self.distances(&found.states, &companion.states));
         let distances = distances.unwrap_or_default().into_iter();
         distances
