@@ -78,7 +78,7 @@ impl Args {
     }
 }
 
-/// A function that can be written; with underscores it is called so in what is written.
+/// A function that can be written. The alias is its name in modules.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum FunctionName {
     /// Accelerations from Q, v̄ and τ

@@ -43,8 +43,28 @@ fn a_module_in_c_is_a_source_and_a_header_under_the_name_of_the_file() {
 /// Functions are asked for by the names that they have in modules, or with hyphens as all options have.
 #[test]
 fn functions_are_called_as_in_modules_or_with_hyphens() {
-    let written = |name: &str| stdout(&["compile", "scenes/snakeboard.toml", "--function", name]);
-    for name in ["momentum_rates", "speeds_from_momenta", "mass_matrix"] {
+    let written = |name: &str| {
+        stdout(&[
+            "compile",
+            "scenes/double_ball_pendulum.toml",
+            "--function",
+            name,
+        ])
+    };
+    let names = [
+        "forward_dynamics",
+        "inverse_dynamics",
+        "mass_matrix",
+        "bias_forces",
+        "momentum_rates",
+        "speeds_from_momenta",
+        "forward_dynamics_derivatives",
+        "inverse_dynamics_derivatives",
+        "inverse_mass_matrix",
+        "forward_dynamics_second_derivatives",
+        "inverse_dynamics_second_derivatives",
+    ];
+    for name in names {
         let module = written(name);
         assert!(module.contains(&format!("pub fn {name}<")), "{module}");
         assert_eq!(written(&name.replace('_', "-")), module);

@@ -110,22 +110,20 @@ impl Tables {
         }
     }
 
-    /// Numbers that are needed beside those for solutions, so many.
-    pub fn room(&self, solution: usize) -> usize {
+    /// Numbers that loops need room for beside those of solutions.
+    pub fn room_besides(&self) -> usize {
         let [freedoms, speeds] = self.places.sizes;
         let width = self.size[1];
         match self.product {
-            Product::SecondForward => {
-                solution + speeds * width + width + 4 * (freedoms + speeds).pow(2)
-            }
-            _ => solution,
+            Product::SecondForward => speeds * width + width + 4 * (freedoms + speeds).pow(2),
+            _ => 0,
         }
     }
 
     /// Numbers that loops of one state need room for.
     pub fn room_of_one(&self) -> usize {
-        let solution = |columns| self.room(room_to_solve(self.above.len(), columns));
-        self.solved_columns().map_or(0, solution)
+        let solution = |columns| room_to_solve(self.above.len(), columns);
+        self.solved_columns().map_or(0, solution) + self.room_besides()
     }
 
     /// Numbers of eight states that loops side by side need room for.

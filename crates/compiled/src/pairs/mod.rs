@@ -140,7 +140,7 @@ impl Pairs<'_> {
     /// M̄⁻¹ by rows; rows of rates that are given are 0. `room` has as many zeros as [`room_to_solve`] says.
     pub fn inverse_mass<T: Scalar>(&self, work: &[T], room: &mut [T], rows: &mut [T]) {
         let size = self.size();
-        let (mut factors, mut sides) = self.split(room, size);
+        let [mut factors, mut sides] = self.split(room, size);
         for speed in 0..size {
             let given = self.held.iter().any(|&[held, _]| held == speed);
             let place = speed * sides.stride + speed;
@@ -161,17 +161,17 @@ impl Pairs<'_> {
     /// Rows of derivatives of forward dynamics, `width` numbers each: in all degrees of freedom, in all speeds, in all efforts, and the rates.
     /// `room` has as many zeros as [`room_to_solve`] says.
     pub fn forward<T: Scalar>(&self, work: &[T], room: &mut [T], rows: &mut [T], width: usize) {
-        let (mut factors, mut sides) = self.split(room, width);
+        let [mut factors, mut sides] = self.split(room, width);
         self.right_hand_sides(work, sides.entries, sides.stride);
         self.fill_mass(work, factors.entries, factors.stride);
-        self.hold(&mut factors, &mut sides, width - 1);
+        self.hold(&mut factors, &mut sides);
         self.factorise(&mut factors);
         self.solve(&factors, &mut sides);
         self.finish(&sides, rows, width);
         add(self.followed, work, rows, width);
     }
 
-    /// What forward dynamics is solved for, in rows of zeros `width` apart: opposites of derivatives of inverse dynamics, S̄ᵀ and the rates.
+    /// What forward dynamics is solved for, in rows of zeros `width` apart: opposites of derivatives of inverse dynamics, and S̄ᵀ.
     pub fn right_hand_sides<T: Scalar>(&self, work: &[T], rows: &mut [T], width: usize) {
         // Zeros stay positive, so that it does not show whether they are skipped.
         self.fill_slopes(work, rows, width, |entry| T::zero() - entry);

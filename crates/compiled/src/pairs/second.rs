@@ -31,7 +31,7 @@ impl Pairs<'_> {
         let (sums, bends) = more.split_at_mut(width);
         self.fill_bends(work, bends, wide);
         self.fill_slopes(work, needed, width, |entry| entry);
-        let (mut factors, mut sides) = self.split(room, freedoms);
+        let [mut factors, mut sides] = self.split(room, freedoms);
         self.fill_mass(work, factors.entries, factors.stride);
         self.factorise(&mut factors);
         for speed in 0..size {

@@ -8,15 +8,8 @@ use hamel_runtime::scalar::Scalar;
 #[repr(align(64))]
 pub struct Aligned<T, const N: usize>(pub [T; N]);
 
-/// M̄, then its factors, by rows.
-pub(super) struct Factors<'a, T> {
-    pub(super) entries: &'a mut [T],
-    /// Numbers of a row: blocks of columns end within it.
-    pub(super) stride: usize,
-}
-
-/// Right-hand sides, then what they are solved to, by rows.
-pub(super) struct RightHandSides<'a, T> {
+/// A matrix by rows: M̄, then its factors; right-hand sides, then what they are solved to.
+pub(super) struct Rows<'a, T> {
     pub(super) entries: &'a mut [T],
     /// Numbers of a row: blocks of columns end within it.
     pub(super) stride: usize,
@@ -59,27 +52,15 @@ impl Pairs<'_> {
         &self,
         room: &'r mut [T],
         columns: usize,
-    ) -> (Factors<'r, T>, RightHandSides<'r, T>) {
+    ) -> [Rows<'r, T>; 2] {
         let (size, [own, other]) = (self.size(), [self.size(), columns].map(stride));
         let (entries, sides) = room.split_at_mut(size * own);
-        let factors = Factors {
-            entries,
-            stride: own,
-        };
-        let sides = RightHandSides {
-            entries: &mut sides[..size * other],
-            stride: other,
-        };
-        (factors, sides)
+        let sides = &mut sides[..size * other];
+        [(entries, own), (sides, other)].map(|(entries, stride)| Rows { entries, stride })
     }
 
-    /// Makes given rates known: what they take of others moves to the right-hand side. They stand in the column `rates`.
-    pub(super) fn hold<T: Scalar>(
-        &self,
-        matrix: &mut Factors<'_, T>,
-        sides: &mut RightHandSides<'_, T>,
-        rates: usize,
-    ) {
+    /// Makes given rates known: what they take of others moves to the right-hand side.
+    pub(super) fn hold<T: Scalar>(&self, matrix: &mut Rows<'_, T>, sides: &mut Rows<'_, T>) {
         let width = sides.stride;
         for &[speed, column] in self.held {
             for row in 0..self.size() {
@@ -88,7 +69,7 @@ impl Pairs<'_> {
             }
         }
         for &[speed, _] in self.held {
-            sides.entries[speed * width..][..rates].fill(T::zero());
+            sides.entries[speed * width..][..width].fill(T::zero());
         }
         for &[speed, column] in self.held {
             sides.entries[speed * width + column] = T::one();
@@ -97,7 +78,7 @@ impl Pairs<'_> {
     }
 
     /// Rates that are given depend on nothing.
-    pub(super) fn fix<T: Scalar>(&self, matrix: &mut Factors<'_, T>) {
+    pub(super) fn fix<T: Scalar>(&self, matrix: &mut Rows<'_, T>) {
         let stride = matrix.stride;
         for &[speed, _] in self.held {
             for other in 0..self.size() {
@@ -109,7 +90,7 @@ impl Pairs<'_> {
     }
 
     /// `M̄ = LᵀDL`, which fills no zero of the tree: L left of the diagonal, D⁻¹ on it. Right of it nothing is read.
-    pub(super) fn factorise<T: Scalar>(&self, matrix: &mut Factors<'_, T>) {
+    pub(super) fn factorise<T: Scalar>(&self, matrix: &mut Rows<'_, T>) {
         let stride = matrix.stride;
         for i in (0..self.size()).rev() {
             let end = self::stride(i + 1);
@@ -135,7 +116,7 @@ impl Pairs<'_> {
     #[inline(never)]
     fn eliminate<T: Scalar, const N: usize>(
         below: &[[usize; 2]],
-        matrix: &mut Factors<'_, T>,
+        matrix: &mut Rows<'_, T>,
         row: usize,
         from: usize,
     ) {
@@ -154,11 +135,7 @@ impl Pairs<'_> {
     }
 
     /// `M̄⁻¹` times the columns of the tables, as many at once as registers take.
-    pub(super) fn solve<T: Scalar>(
-        &self,
-        factors: &Factors<'_, T>,
-        sides: &mut RightHandSides<'_, T>,
-    ) {
+    pub(super) fn solve<T: Scalar>(&self, factors: &Rows<'_, T>, sides: &mut Rows<'_, T>) {
         let mut done = 0;
         for &[from, to] in self.columns {
             let (from, to) = (done.max(from / BLOCK * BLOCK), stride(to));
@@ -177,8 +154,8 @@ impl Pairs<'_> {
     /// A column of M̄⁻¹ is a unit below its diagonal, and not wanted there: rows begin at the block of the diagonal.
     fn solve_strip<T: Scalar>(
         &self,
-        factors: &Factors<'_, T>,
-        sides: &mut RightHandSides<'_, T>,
+        factors: &Rows<'_, T>,
+        sides: &mut Rows<'_, T>,
         [from, to]: [usize; 2],
     ) {
         let mirrored = self.mirrored.filter(|&first| first <= from);
@@ -204,16 +181,15 @@ impl Pairs<'_> {
     #[inline(never)]
     fn solve_up<T: Scalar, const N: usize>(
         below: &[[usize; 2]],
-        factors: &Factors<'_, T>,
-        sides: &mut RightHandSides<'_, T>,
+        factors: &Rows<'_, T>,
+        sides: &mut Rows<'_, T>,
         (row, column): (usize, usize),
         end: usize,
     ) {
         let mut own: [T; N] = *super::numbers(sides.row(row), column);
         for &[from, to] in below {
             let to = to.min(end).max(from);
-            let factors = factors.entries[from * factors.stride..to * factors.stride]
-                .chunks_exact(factors.stride);
+            let factors = factors.rows(from, to);
             for (factors, other) in factors.zip(sides.rows(from, to)).rev() {
                 less(&mut own, factors[row], super::numbers(other, column));
             }
@@ -225,11 +201,11 @@ impl Pairs<'_> {
     #[inline(never)]
     fn solve_down<T: Scalar, const N: usize>(
         above: &[[usize; 2]],
-        factors: &Factors<'_, T>,
-        sides: &mut RightHandSides<'_, T>,
+        factors: &Rows<'_, T>,
+        sides: &mut Rows<'_, T>,
         (row, column): (usize, usize),
     ) {
-        let factors = &factors.entries[row * factors.stride..][..factors.stride];
+        let factors = factors.row(row);
         let mut own: [T; N] = *super::numbers(sides.row(row), column);
         for entry in &mut own {
             *entry *= factors[row];
@@ -243,14 +219,11 @@ impl Pairs<'_> {
     }
 
     /// Assigns the rows of results, `width` numbers each.
-    pub(super) fn finish<T: Scalar>(
-        &self,
-        sides: &RightHandSides<'_, T>,
-        rows: &mut [T],
-        width: usize,
-    ) {
-        let width = width.max(1);
-        let solved = || sides.entries.chunks_exact(sides.stride.max(1));
+    pub(super) fn finish<T: Scalar>(&self, sides: &Rows<'_, T>, rows: &mut [T], width: usize) {
+        if self.size() == 0 {
+            return;
+        }
+        let solved = || sides.rows(0, self.size());
         for (row, own) in rows.chunks_exact_mut(width).zip(solved()) {
             let (blocks, rest) = row.as_chunks_mut::<BLOCK>();
             let (own, _) = own.as_chunks::<BLOCK>();
@@ -273,7 +246,7 @@ impl Pairs<'_> {
     }
 }
 
-impl<T: Scalar> RightHandSides<'_, T> {
+impl<T: Scalar> Rows<'_, T> {
     fn row(&self, row: usize) -> &[T] {
         &self.entries[row * self.stride..][..self.stride]
     }

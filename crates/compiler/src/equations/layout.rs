@@ -386,8 +386,6 @@ impl<'a> Layout<'a> {
         for &[_, column] in &self.tables.held {
             filled[column] = true;
         }
-        // The rates are found already.
-        filled[width - 1] = false;
         filled
     }
 

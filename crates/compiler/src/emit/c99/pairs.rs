@@ -84,11 +84,11 @@ impl Written {
 /// Numbers that loops need room for: M̄, and what is solved where this is no part of the results.
 fn room(tables: &Tables) -> usize {
     let size = tables.above.len();
-    match (tables.solved_columns(), tables.product) {
-        (None, _) => 0,
-        (Some(columns), Product::SecondForward) => tables.room(size * (size + columns)),
-        (Some(_), _) => tables.room(size * size),
-    }
+    let solution = |columns| match tables.product {
+        Product::SecondForward => size * (size + columns),
+        _ => size * size,
+    };
+    tables.solved_columns().map_or(0, solution) + tables.room_besides()
 }
 
 impl Table {

@@ -78,9 +78,6 @@ fn one_state(function: &Function) -> TokenStream {
 
 /// The same with results in rows, one after the other.
 fn rows_of_state(function: &Function) -> TokenStream {
-    if function.columns.is_none() {
-        return one_state(function);
-    }
     let into = into(function);
     quote! {
         |q, v, u, results| {
